@@ -1,3 +1,4 @@
+// Logins from their beginning to a session, and what ends sessions.
 #include "toolchain/tools/gateway/access.hpp"
 
 #include <sys/stat.h>

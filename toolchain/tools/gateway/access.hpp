@@ -1,4 +1,4 @@
-// Who may come in: users, passwords, lock-out and sessions together.
+// Decides who may come in: users, passwords, lock-out and sessions together.
 #pragma once
 
 #include "toolchain/tools/gateway/lockout.hpp"

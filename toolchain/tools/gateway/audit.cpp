@@ -1,3 +1,4 @@
+// Writes, rotates and repairs the log of changes.
 #include "toolchain/tools/gateway/audit.hpp"
 
 #include "toolchain/tools/browser/value.hpp"

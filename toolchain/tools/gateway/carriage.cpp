@@ -1,3 +1,4 @@
+// Requests to a machine and their answers, one log entry each.
 #include "toolchain/tools/gateway/carriage.hpp"
 
 #include "toolchain/tools/gateway/encoding.hpp"

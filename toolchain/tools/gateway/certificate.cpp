@@ -1,3 +1,4 @@
+// Keys and certificates by OpenSSL.
 #include "toolchain/tools/gateway/certificate.hpp"
 
 #include "toolchain/tools/gateway/encoding.hpp"

@@ -1,3 +1,4 @@
+// HTTP by Beast: one request after the other, each within its time and size.
 #include "toolchain/tools/gateway/wire.hpp"
 
 #include "toolchain/tools/gateway/connection.hpp"

@@ -1,3 +1,4 @@
+// Converts texts of the network in both directions.
 #include "toolchain/tools/gateway/encoding.hpp"
 
 #include "kernel/base/utf8.hpp"

@@ -1,3 +1,4 @@
+// Encodes readings, and keeps what a client has.
 #include "toolchain/tools/gateway/frame.hpp"
 
 #include "toolchain/tools/browser/reading_text.hpp"

@@ -1,3 +1,4 @@
+// Passes on what the scout saw, ticks, and starts logins and runs.
 #include "toolchain/tools/gateway/hub.hpp"
 
 #include "toolchain/tools/browser/reading_text.hpp"

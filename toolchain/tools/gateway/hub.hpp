@@ -1,4 +1,4 @@
-// What all clients share: machines, access, the log and the counters. It knows no socket of the network.
+// All that clients share: machines, access, the log and the counters. It knows no socket of the network.
 #pragma once
 
 #include "toolchain/tools/gateway/access.hpp"

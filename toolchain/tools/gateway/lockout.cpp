@@ -1,3 +1,4 @@
+// Counts failures by user and by address.
 #include "toolchain/tools/gateway/lockout.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The table of messages with their fields, and its reader.
 #include "toolchain/tools/gateway/message.hpp"
 
 #include "kernel/base/nearest.hpp"

@@ -1,3 +1,4 @@
+// Writes values, figures and counters as families of metrics.
 #include "toolchain/tools/gateway/metrics.hpp"
 
 #include "toolchain/tools/browser/reading_text.hpp"

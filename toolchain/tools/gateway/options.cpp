@@ -1,3 +1,4 @@
+// Reads the options and refuses combinations that make no sense.
 #include "toolchain/tools/gateway/options.hpp"
 
 #include "toolchain/tools/gateway/sandbox.hpp"

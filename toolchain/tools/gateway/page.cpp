@@ -1,3 +1,4 @@
+// Writes HTML for people and JSON for clients.
 #include "toolchain/tools/gateway/page.hpp"
 
 #include "toolchain/tools/browser/reading_text.hpp"

@@ -1,3 +1,4 @@
+// Obeys the messages of one client.
 #include "toolchain/tools/gateway/peer.hpp"
 
 #include "toolchain/tools/browser/value.hpp"

@@ -1,3 +1,4 @@
+// A gateway's first requests to a machine.
 #include "toolchain/tools/gateway/place.hpp"
 
 #include "toolchain/tools/gateway/bounds.hpp"

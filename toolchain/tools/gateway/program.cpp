@@ -1,3 +1,4 @@
+// Puts the parts of the gateway together, confines the process, and serves.
 #include "toolchain/tools/gateway/program.hpp"
 
 #include "toolchain/tools/gateway/certificate.hpp"
@@ -135,6 +136,47 @@ void keep_memory_small() {
     ::mallopt(M_ARENA_MAX, 2);
 }
 
+/// Returns the context; null on the loopback. `fingerprint` receives the certificate's.
+std::expected<std::shared_ptr<net::ssl::context>, std::string> tls_of(const Options& options,
+                                                                      std::string& fingerprint) {
+    if (options.loopback) return nullptr;
+    CertificateFiles files{options.certificate, options.key};
+    if (options.certificate.empty()) {
+        auto own = own_certificate(options.state, options.address);
+        if (!own) return std::unexpected(own.error());
+        files = std::move(*own);
+    }
+    return tls_context(files, fingerprint);
+}
+
+/// The network's thread and the others, once they are there.
+struct Threads {
+    net::io_context* network = nullptr;
+    Workers* logins = nullptr;
+    Workers* runs = nullptr;
+};
+
+Outside outside_of(const Threads& threads, const Options& options) {
+    Outside outside;
+    outside.connect = [&threads](const std::string& socket, OnPacket receive, std::string& fault) {
+        return connect_relay(*threads.network, socket, std::move(receive), fault);
+    };
+    outside.in_background = [&threads](std::function<bool()> work, std::function<void(bool)> done) {
+        return threads.logins->post([&threads, work = std::move(work), done = std::move(done)] {
+            net::post(*threads.network, [done, result = work()] { done(result); });
+        });
+    };
+    outside.start = [&threads](std::function<void()> work) {
+        static_cast<void>(threads.runs->post(std::move(work)));
+    };
+    outside.on_network = [&threads](std::function<void()> what) {
+        net::post(*threads.network, std::move(what));
+    };
+    outside.directory = options.directory;
+    outside.black_boxes = options.black_boxes;
+    return outside;
+}
+
 } // namespace
 
 int serve(const Options& options, std::ostream& out, std::ostream& errors) {
@@ -148,39 +190,16 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
                     "' for the sockets of machines; make it, or name another with --directory");
     auto access = access_of(options);
     if (!access) return fail(access.error());
-    std::shared_ptr<net::ssl::context> tls;
     std::string fingerprint;
-    if (!options.loopback) {
-        auto files = options.certificate.empty() ? own_certificate(options.state, options.address)
-                                                 : std::expected<CertificateFiles, std::string>{
-                                                       CertificateFiles{options.certificate, options.key}};
-        if (!files) return fail(files.error());
-        auto context = tls_context(*files, fingerprint);
-        if (!context) return fail(context.error());
-        tls = std::move(*context);
-    }
+    const auto tls = tls_of(options, fingerprint);
+    if (!tls) return fail(tls.error());
 
     // The hub outlives the io_context, whose connections use it to their end.
-    net::io_context* io_at = nullptr;
-    Workers* workers_at = nullptr;
-    Workers* runners_at = nullptr;
-    Outside outside;
-    outside.connect = [&io_at](const std::string& socket, OnPacket receive, std::string& fault) {
-        return connect_relay(*io_at, socket, std::move(receive), fault);
-    };
-    outside.in_background = [&](std::function<bool()> work, std::function<void(bool)> done) {
-        return workers_at->post([&io_at, work = std::move(work), done = std::move(done)] {
-            net::post(*io_at, [done, result = work()] { done(result); });
-        });
-    };
-    outside.start = [&](std::function<void()> work) { static_cast<void>(runners_at->post(std::move(work))); };
-    outside.on_network = [&](std::function<void()> what) { net::post(*io_at, std::move(what)); };
-    outside.directory = options.directory;
-    outside.black_boxes = options.black_boxes;
-    Hub hub{std::move(*access), options.log, std::move(outside)};
+    Threads threads;
+    Hub hub{std::move(*access), options.log, outside_of(threads, options)};
     net::io_context io{1};
-    io_at = &io;
-    Server server{io, hub, tls.get()};
+    threads.network = &io;
+    Server server{io, hub, tls->get()};
     if (const std::string fault = server.listen(options.address, options.port); !fault.empty())
         return fail(fault);
     net::signal_set signals{io, SIGTERM, SIGINT};
@@ -198,10 +217,10 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
         errors << "tappet-gateway: this kernel has no " << each << "; the gateway runs without it"
                << std::endl;
 
-    Workers workers{bounds.logins_at_once, bounds.logins_waiting};
-    workers_at = &workers;
-    Workers runners{bounds.runs, bounds.runs};
-    runners_at = &runners;
+    Workers logins{bounds.logins_at_once, bounds.logins_waiting};
+    Workers runs{bounds.runs, bounds.runs};
+    threads.logins = &logins;
+    threads.runs = &runs;
     ScoutThread scouts{std::move(scout), [&](std::vector<Sighting> found) {
                            net::post(io, [&hub, found = std::move(found)] { hub.see(found); });
                        }};

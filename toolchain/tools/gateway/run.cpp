@@ -1,3 +1,4 @@
+// Runs a browser's command on its thread, with streams that wait for the client.
 #include "toolchain/tools/gateway/run.hpp"
 
 #include "toolchain/tools/browser/value.hpp"

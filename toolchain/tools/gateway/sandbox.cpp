@@ -1,3 +1,4 @@
+// Limits, Landlock, capabilities and seccomp (see landlock(7), seccomp(2)).
 #include "toolchain/tools/gateway/sandbox.hpp"
 
 #include "toolchain/tools/gateway/bounds.hpp"

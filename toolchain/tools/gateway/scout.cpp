@@ -1,3 +1,4 @@
+// Compares the sockets of a directory with those known.
 #include "toolchain/tools/gateway/scout.hpp"
 
 #include "toolchain/tools/gateway/encoding.hpp"

@@ -1,3 +1,4 @@
+// Calls OpenSSL.
 #include "toolchain/tools/gateway/secrets.hpp"
 
 #include <cstdio>

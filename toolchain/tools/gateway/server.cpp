@@ -1,3 +1,4 @@
+// Accepts connections by asio, and counts them by address.
 #include "toolchain/tools/gateway/server.hpp"
 
 #include "toolchain/tools/gateway/connection.hpp"

@@ -1,3 +1,4 @@
+// Keeps sessions by the digests of their tokens.
 #include "toolchain/tools/gateway/sessions.hpp"
 
 #include "toolchain/tools/gateway/encoding.hpp"

@@ -1,3 +1,4 @@
+// Routes requests, and checks origins, cookies and passwords.
 #include "toolchain/tools/gateway/site.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -80,7 +81,7 @@ std::string Site::cookie(std::string_view token, bool over) const {
 }
 
 std::string Site::fault_in_origin(const HttpRequest& request, bool needed) const {
-    // Whoever has no users file trusts the loopback, so no other name may lead there (DNS rebinding).
+    // Without a users file the gateway trusts the loopback, so no other name may lead there (DNS rebinding).
     if (hub_.access().local() && !is_loopback(request.host))
         return "this gateway is for the loopback; use the address 127.0.0.1, [::1] or localhost";
     if (request.origin.empty())

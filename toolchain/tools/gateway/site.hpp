@@ -34,7 +34,7 @@ struct HttpReply {
     std::vector<std::pair<std::string, std::string>> headers{};
 };
 
-/// Who comes by a WebSocket; nobody: the client logs in by message.
+/// The user who comes by a WebSocket; nobody: the client logs in by message.
 struct Admission {
     std::optional<LoggedIn> who{};
     std::string token{};

@@ -1,3 +1,4 @@
+// A seqpacket socket in the io_context.
 #include "toolchain/tools/gateway/socket_relay.hpp"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// Reads the wanted values of a machine together.
 #include "toolchain/tools/gateway/station.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Adds, changes, lists and removes users.
 #include "toolchain/tools/gateway/user_command.hpp"
 
 #include "toolchain/tools/gateway/users.hpp"

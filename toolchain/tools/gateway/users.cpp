@@ -1,3 +1,4 @@
+// Reads and writes the users file.
 #include "toolchain/tools/gateway/users.hpp"
 
 #include "toolchain/tools/gateway/bounds.hpp"

@@ -1,3 +1,4 @@
+// WebSockets by Beast, with a bounded queue.
 #include "toolchain/tools/gateway/web_socket.hpp"
 
 #include "toolchain/tools/gateway/encoding.hpp"

@@ -1,3 +1,4 @@
+// Threads that take tasks from one queue.
 #include "toolchain/tools/gateway/workers.hpp"
 
 namespace tappet::network {
