@@ -33,12 +33,12 @@ install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/t
 install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign" PATTERN "*-aarch64" EXCLUDE)
 
 # They find each other beside themselves.
-install(TARGETS tappet tappet-bench tappet-browse tappet-effects tappet-image tappet-tables bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
+install(TARGETS tappet tappet-bench tappet-browse tappet-effects tappet-gateway tappet-image tappet-tables bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
 install(FILES "${CMAKE_BINARY_DIR}/tools/box-init.inputs" DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet") # for bills of materials
 install(CODE "
     set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
     file(MAKE_DIRECTORY \"\${bin}\")
-    foreach(program IN ITEMS tappet tappet-browse tappet-bench)
+    foreach(program IN ITEMS tappet tappet-browse tappet-bench tappet-gateway)
         file(CREATE_LINK \"../${CMAKE_INSTALL_LIBDIR}/tappet/\${program}\" \"\${bin}/\${program}\" SYMBOLIC)
     endforeach()")
 
