@@ -14,8 +14,8 @@ using Tcp = net::ip::tcp;
 using boost::system::error_code;
 
 struct Server::Inside : std::enable_shared_from_this<Inside> {
-    Inside(net::io_context& io, Hub& hub, net::ssl::context* context)
-        : hub{hub}, tls{context}, site{hub, context != nullptr}, acceptor{io}, pause{io} {}
+    Inside(net::io_context& io, Hub& shared, net::ssl::context* context)
+        : hub{shared}, tls{context}, site{shared, context != nullptr}, acceptor{io}, pause{io} {}
 
     void accept() {
         acceptor.async_accept([self = shared_from_this()](error_code error, Tcp::socket socket) {

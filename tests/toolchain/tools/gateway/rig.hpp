@@ -45,7 +45,7 @@ public:
     void tick(int ticks = 1) {
         for (int i = 0; i < ticks; ++i) hub.tick(now += bounds.tick);
     }
-    std::shared_ptr<Peer> join(Client& client,
+    std::shared_ptr<Peer> join(Outlet& client,
                                std::optional<LoggedIn> who = LoggedIn{"mary", Role::engineer}) {
         return std::make_shared<Peer>(hub, client, "10.0.0.1", std::move(who), std::string{}, now);
     }
