@@ -153,10 +153,8 @@ struct Bus {
     }
 
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
-
     /// Drops what is queued for sending.
     void purge() noexcept TAPPET_REALTIME { device_->purge(); }
-
     void send_cyclic(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (due_[f] > cycle.now) continue;
@@ -232,7 +230,6 @@ private:
     static constexpr bool is_cyclic(std::size_t f) noexcept {
         return map.frames[f].direction == Direction::transmit && map.frames[f].every > Duration::zero();
     }
-
     static constexpr bool is_on_demand(std::size_t f) noexcept {
         return map.frames[f].direction == Direction::transmit && map.frames[f].every == Duration::zero();
     }
@@ -329,10 +326,7 @@ private:
         if (bad == was_faulted_) return;
         was_faulted_ = bad;
         is_faulted.write(bad);
-        if (bad) {
-            bus_fault.emit();
-            return;
-        }
+        if (bad) return bus_fault.emit();
         forget_demands();
         for (std::size_t f = 0; f < frame_count; ++f)
             if (due_[f] <= now) next_period(f, now);
@@ -402,11 +396,10 @@ private:
         const bool repeats = found.usable && !found.agreed && may_repeat_[f] && !found.held;
         may_repeat_[f] = found.usable && found.agreed;
         if (!found.usable) return;
-        if (!repeats && !keep_inputs(f)) {
+        if (repeats || keep_inputs(f))
+            send_stored(f, now, Keep::latest);
+        else
             may_repeat_[f] = false;
-            return;
-        }
-        send_stored(f, now, Keep::latest);
     }
 
     /// Sends the demanded frames; returns false when there were none.
