@@ -227,7 +227,9 @@ Result<std::unique_ptr<FarWire>> FarWire::open(const Address& address, const Tru
     Secret stream{*context, *tls};
     if (const auto done = connect(*context, beast::get_lowest_layer(stream), address); !done)
         return std::unexpected(done.error());
-    SSL_set_tlsext_host_name(stream.native_handle(), address.host.c_str());
+    // OpenSSL's macro SSL_set_tlsext_host_name, without its cast.
+    SSL_ctrl(stream.native_handle(), SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name,
+             const_cast<char*>(address.host.c_str()));
     const error_code error = await(*context, [&](auto done) {
         stream.async_handshake(asio::ssl::stream_base::client, std::move(done));
     });
