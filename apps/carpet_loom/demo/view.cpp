@@ -38,7 +38,7 @@ browser::WatchPicture picture_of(const Story& story, std::int64_t picks_wanted, 
 
 View::View(bool plain, std::int64_t picks_wanted) : picks_wanted_{picks_wanted} {
     if (!plain && browser::Screen::possible())
-        screen_.emplace();
+        screen_ = browser::own_screen();
     else
         put("booting the emulated box");
 }

@@ -5,7 +5,7 @@
 #include "toolchain/tools/browser/screen.hpp"
 
 #include <chrono>
-#include <optional>
+#include <memory>
 
 namespace tappet::demo {
 
@@ -22,12 +22,12 @@ public:
     void tick(const Story& story);
     /// Restores the terminal.
     void finish() { screen_.reset(); }
-    [[nodiscard]] bool draws() const { return screen_.has_value(); }
+    [[nodiscard]] bool draws() const { return screen_ != nullptr; }
 
 private:
     using Steady = std::chrono::steady_clock;
 
-    std::optional<browser::Screen> screen_;
+    std::unique_ptr<const browser::Screen> screen_;
     std::int64_t picks_wanted_;
     Steady::time_point begun_ = Steady::now(), drawn_at_{};
     std::size_t stops_told_ = 0;
