@@ -20,7 +20,7 @@ struct Rig : press::BrowsedPress<press::line_table> {
         auto& interpreter = *instance.find<CommandInterpreter>("interpreter");
         const LineFunctions& functions = CommandInterpreter::line_functions;
         LineRefusal refusal{};
-        const Sentence fault = functions.begin(&interpreter, line, role, refusal);
+        const Sentence fault = functions.begin(&interpreter, line, {role, Origin::local}, refusal);
         demand(fault.empty() == (refusal == LineRefusal::none));
         if (!fault.empty()) return false;
         for (int i = 0; i < 10 && functions.end(&interpreter) == nullptr; ++i) run(20ms);
