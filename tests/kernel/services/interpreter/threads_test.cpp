@@ -28,7 +28,7 @@ struct Typist : Onlooker {
         }
         LineRefusal refusal{};
         is_at_work_ =
-            functions.begin(&interpreter, lines[typed_ % std::size(lines)], Role::engineer, refusal).empty();
+            functions.begin(&interpreter, lines[typed_ % std::size(lines)], Rights{}, refusal).empty();
         if (is_at_work_) ++typed_;
         looks_ = 0;
     }
