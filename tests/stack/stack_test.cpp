@@ -52,7 +52,7 @@ const Rules rules{
     .ends = {"contract_broken", "break_contract", "__assert_fail", "__stack_chk_fail", "abort", "__libc_message", "std::terminate",
              "__throw_", "__cxa_", "_Unwind_", "__libc_fatal", "pthread_exit"},
     // The main thread calls these: arming, opening devices, the end; so does the guardian.
-    .outside = {"::analyse_traffic(", "::longest_seen(", "os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "ExtraSection::", "Limits<", "Control<", "RealWorld::", "MakersThread::", "Activity::enter(", "MachineInstance",
+    .outside = {"::analyse_traffic(", "::longest_seen(", "::gate_output(", "MachineBuilder::construct()::", "os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "ExtraSection::", "Limits<", "Control<", "RealWorld::", "MakersThread::", "Activity::enter(", "MachineInstance",
                 "tappet::Hardware<", "tappet::OpenedDevices::", "::RealBus::", "::RealChip::", "::RealServer::", "::RealPort::", "tappet::RealDevice::", "tappet::DeviceAsked const&", "os::Guard::try_apart<", "tappet::make_safe_requests(", "::GuardedProcess::", "tappet::end_safely(", "BrowserService::answer_for_nobody", "run_firmware(", "Probe::wake(", "Probe::load(", "os::build_id()", "cpf::is_blank"},
     .stated = {
         {picked_at_start, 256, "bytes copied or compared: libc picks the function for the processor, none has a frame to speak of"},
