@@ -26,15 +26,16 @@ Client* Connections::accept() noexcept {
         // A gateway that has not named its user yet takes nobody's place.
         const BoardRole* const gateway = gateway_of(*peer, board_);
         const Role role = gateway != nullptr ? Role::observer : role_of(*peer, board_);
-        Client* place = place_for(role);
+        Client* place = place_for(role, gateway);
         if (place == nullptr) {
             turn_away(connection, Sentence{"all ", max_clients,
                                            " places are taken; end another browser of this machine"});
             continue;
         }
         if (place->serial != 0) {
-            turn_away(place->connection,
-                      Sentence{"an ", to_text(role), " needs this place; connect again later"});
+            const Sentence who = gateway != nullptr ? Sentence{"another user of your gateway"}
+                                                    : Sentence{"an ", to_text(role)};
+            turn_away(place->connection, Sentence{who, " needs this place; connect again later"});
             disconnect(*place);
         }
         *place = Client{.connection = std::move(connection),
@@ -49,12 +50,14 @@ Client* Connections::accept() noexcept {
     return nullptr;
 }
 
-/// Returns a free place, or that of a client with a lower role.
-Client* Connections::place_for(Role role) noexcept {
+/// Returns a free place, or that of a client with a lower role. The role of a gateway's user is not known
+/// yet: it may be higher than that of the gateway's own observers, which must not block it.
+Client* Connections::place_for(Role role, const BoardRole* gateway) noexcept {
     Client* best = nullptr;
     for (Client& each : clients_) {
         if (each.serial == 0) return &each;
-        if (each.rights.role >= role) continue;
+        const bool is_own = gateway != nullptr && each.gateway == gateway;
+        if (each.rights.role >= role && !(is_own && each.rights.role == Role::observer)) continue;
         if (best == nullptr || each.rights.role < best->rights.role ||
             (each.rights.role == best->rights.role && each.heard < best->heard))
             best = &each;

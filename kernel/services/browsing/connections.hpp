@@ -39,8 +39,8 @@ public:
     [[nodiscard]] bool is_open() const noexcept { return listener_.open(); }
 
     /// Accepts a waiting client. When all places are taken, a client with a higher role gets the place of the
-    /// longest idle client of the lowest role; a client that loses its place, or gets none, is told so and
-    /// disconnected: `turned_away` counts them.
+    /// longest idle client of the lowest role, and a gateway's that of its own observer; a client that loses
+    /// its place, or gets none, is told so and disconnected: `turned_away` counts them.
     [[nodiscard]] Client* accept() noexcept;
     [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
 
@@ -54,7 +54,7 @@ public:
     void disconnect(Client& client) noexcept;
 
 private:
-    [[nodiscard]] Client* place_for(Role role) noexcept;
+    [[nodiscard]] Client* place_for(Role role, const BoardRole* gateway) noexcept;
     void turn_away(const os::LocalConnection& connection, const Sentence& why) noexcept;
 
     os::LocalListener listener_{};

@@ -171,5 +171,16 @@ TEST_F(Gateway, new_connection_takes_nobody_s_place) {
     for (const auto& each : observers) EXPECT_TRUE(has(ask(*each, "1 hello"), R"("ok": true)"));
 }
 
+TEST_F(Gateway, observer_does_not_block_the_other_users_of_his_gateway) {
+    std::vector<std::unique_ptr<Talker>> idle;
+    for (std::size_t i = 0; i < browsing::max_clients; ++i) {
+        idle.push_back(std::make_unique<Talker>(path(), panel_gateway));
+        EXPECT_TRUE(has(ask(*idle.back(), "1 as eve observer network"), "observer"));
+    }
+    as(panel_gateway, "mary engineer network", "engineer");
+    EXPECT_TRUE(has(idle.front()->receive(), "another user of your gateway needs this place"));
+    EXPECT_TRUE(has(ask(*idle[1], "2 hello"), R"("ok": true)"));
+}
+
 } // namespace
 } // namespace tappet::press

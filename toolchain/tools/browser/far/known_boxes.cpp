@@ -2,6 +2,7 @@
 #include "toolchain/tools/browser/far/known_boxes.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -9,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -33,7 +35,11 @@ std::string append(const std::string& file, const std::string& line) {
 
 } // namespace
 
-bool Address::is_loopback() const { return host == "localhost" || host == "::1" || host.starts_with("127."); }
+bool Address::is_loopback() const {
+    in_addr number{}; // a name such as 127.mill.example is no number
+    return host == "localhost" || host == "::1" ||
+           (host.starts_with("127.") && ::inet_pton(AF_INET, host.c_str(), &number) == 1);
+}
 
 std::optional<Address> parse_address(std::string_view word) {
     const std::size_t colon = word.rfind(':');
@@ -52,7 +58,11 @@ std::optional<Address> parse_address(std::string_view word) {
                })) {
         return std::nullopt;
     }
-    return Address{std::string{host}, std::string{port}, std::string{word}};
+    std::string written{word};
+    std::ranges::transform(written, written.begin(),
+                           [](unsigned char each) { return static_cast<char>(std::tolower(each)); });
+    std::string lower = written.substr(static_cast<std::size_t>(host.data() - word.data()), host.size());
+    return Address{std::move(lower), std::string{port}, std::move(written)};
 }
 
 std::string KnownBoxes::usual_file() {
@@ -60,6 +70,13 @@ std::string KnownBoxes::usual_file() {
     const char* const home = std::getenv("HOME");
     if (config != nullptr && *config != 0) return std::string{config} + "/tappet/known_boxes";
     return home == nullptr || *home == 0 ? "" : std::string{home} + "/.config/tappet/known_boxes";
+}
+
+bool KnownBoxes::knows(const Address& address) const {
+    std::ifstream known{file_};
+    for (std::string line; std::getline(known, line);)
+        if (line.starts_with(address.text + " ")) return true;
+    return false;
 }
 
 Result<std::string> KnownBoxes::check(const Address& address, const std::string& fingerprint) {

@@ -233,8 +233,9 @@ Result<std::unique_ptr<FarWire>> FarWire::open(const Address& address, const Tru
     const error_code error = await(*context, [&](auto done) {
         stream.async_handshake(asio::ssl::stream_base::client, std::move(done));
     });
-    if (error && address.is_loopback() && trust.ca.empty())
-        return open_plain(address); // it may be one of --loopback
+    // It may be a gateway of --loopback, but not one that had a certificate before.
+    if (error && address.is_loopback() && trust.ca.empty() && !KnownBoxes{trust.known}.knows(address))
+        return open_plain(address);
     if (error) return std::unexpected(refused(address, trust, stream, error));
     if (trust.ca.empty()) {
         const auto known = KnownBoxes{trust.known}.check(address, fingerprint_of(stream));

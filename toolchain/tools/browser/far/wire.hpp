@@ -21,7 +21,8 @@ public:
     virtual ~FarWire() = default;
 
     /// Connects by TLS 1.3 and checks the certificate. At this host's loopback interface a gateway without
-    /// TLS is accepted. `notes`: tells of a new box. Not longer than 10 s for each step.
+    /// TLS is accepted, unless it is a known box. `notes`: tells of a new box. Not longer than 10 s for each
+    /// step.
     static Result<std::unique_ptr<FarWire>> open(const Address& address, const Trust& trust,
                                                  std::ostream& notes);
 

@@ -102,6 +102,9 @@ TEST(FarCallOf, words_is_one_when_the_first_is_an_address) {
     EXPECT_FALSE(of({"mill-7:8443", "--ca"}));
     EXPECT_TRUE(parse_address("127.0.0.1:80")->is_loopback());
     EXPECT_FALSE(parse_address("128.0.0.1:80")->is_loopback());
+    EXPECT_FALSE(parse_address("127.mill.example:80")->is_loopback());
+    EXPECT_TRUE(parse_address("LocalHost:80")->is_loopback());
+    EXPECT_EQ(parse_address("LocalHost:80")->text, "localhost:80") << "a box is known by one name";
 }
 
 TEST_F(FarClient, logs_in_and_shows_what_the_line_prints_with_its_exit_code) {

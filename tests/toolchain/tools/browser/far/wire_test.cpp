@@ -217,6 +217,8 @@ TEST_F(FarWires, accept_no_tls_at_the_loopback_interface_only_without_an_authori
     Address elsewhere = server.address();
     elsewhere.host = "0.0.0.0"; // the same interface, by an address that is not its own
     EXPECT_THAT(refusal(elsewhere, pinned), HasSubstr("no TLS 1.3 with"));
+    ASSERT_TRUE(KnownBoxes{pinned.known}.check(server.address(), "sha256:aa"));
+    EXPECT_THAT(refusal(server.address(), pinned), HasSubstr("no TLS 1.3 with")) << "it had a certificate";
 }
 
 TEST_F(FarWires, say_what_is_at_the_address) {
