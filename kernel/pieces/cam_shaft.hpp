@@ -28,6 +28,13 @@ namespace tappet {
 /// absence of codes (`wakes, stale_after(..)`). Real-time.
 template <const auto& cams> struct CamShaft {
     static constexpr std::size_t count = cams.size();
+    /// Of each row: the number of windows before it.
+    static constexpr auto window_of = [] {
+        std::array<std::size_t, count + 1> before{};
+        for (std::size_t i = 0; i < count; ++i) before[i + 1] = before[i] + (cams.rows[i].is_window ? 1 : 0);
+        return before;
+    }();
+    static constexpr std::size_t window_count = window_of[count];
     static constexpr Sentence cam_fault = check(cams.view());
     static constexpr std::string_view device_fault = cam_fault.view();
 
@@ -36,7 +43,8 @@ template <const auto& cams> struct CamShaft {
     Output<double> angle_deg, speed_rpm;
     Output<std::int64_t> fired, skipped;
     Output<bool> valid;
-    std::array<Event<>, count> enters, leaves;
+    std::array<Event<>, count> enters;
+    std::array<Event<>, window_count> leaves;
     Event<> lost;
     Timer cam_timer;
     Property<std::int64_t> codes_per_turn{4096}, counter_bits{0};
@@ -87,7 +95,7 @@ template <const auto& cams> struct CamShaft {
             all[n++] = edge<&CamShaft::enters>(is_window ? enters_names[i].view() : cams.rows[i].name, i,
                                                "to be driven now, to act at its angle");
             if (is_window)
-                all[n++] = edge<&CamShaft::leaves>(leaves_names[i].view(), i,
+                all[n++] = edge<&CamShaft::leaves>(leaves_names[i].view(), window_of[i],
                                                    "no longer; also when the shaft stands or is lost");
         }
         for (const Facet& each :
@@ -113,11 +121,7 @@ template <const auto& cams> struct CamShaft {
     }
 
 private:
-    static constexpr std::size_t edge_count = [] {
-        std::size_t n = 0;
-        for (const CamRow& row : cams.rows) n += row.is_window ? 2 : 1;
-        return n;
-    }();
+    static constexpr std::size_t edge_count = count + window_count;
     static constexpr auto names(std::string_view ending) {
         std::array<FacetName, count> all{};
         for (std::size_t i = 0; i < count; ++i) all[i] = {cams.rows[i].name, ending};
@@ -166,7 +170,7 @@ private:
     }
     void tell(const CamEvent& event) noexcept TAPPET_REALTIME {
         if (event.kind == CamKind::leave) {
-            leaves[event.row].emit();
+            leaves[window_of[event.row]].emit();
         } else if (enabled.get()) {
             fired.write(fired.last() + 1);
             enters[event.row].emit();
@@ -181,7 +185,7 @@ private:
     /// Resets as if no code had ever arrived.
     void rest() noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < count; ++i)
-            if (cams.rows[i].is_window) leaves[i].emit();
+            if (cams.rows[i].is_window) leaves[window_of[i]].emit();
         estimator_ = ShaftEstimator{shaft_};
         schedule_ = CamSchedule<count>{cams};
         cam_timer.cancel();

@@ -44,6 +44,8 @@ struct SmallPump : Pump {
     void changed() noexcept TAPPET_REALTIME { changes += 100; }
     static constexpr auto interface() {
         return facets(property<&SmallPump::limit>("most", "bar", "of the pressure", range(0, 5)),
+                      property<&SmallPump::least>("least", "bar", "of the pressure", range(0, 5)),
+                      property<&SmallPump::mode>("mode", "", "of the motor"),
                       setter<&SmallPump::limit>("set_limit", "by a peer"),
                       getter<&SmallPump::limit>("get_limit", "for a peer"));
     }
