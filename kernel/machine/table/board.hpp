@@ -152,19 +152,21 @@ template <class... Devices>
 constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
     return detail::list_of<BoardDevice, 16>(devices...);
 }
+/// The processes of the user of that number.
 constexpr BoardPeer user(std::uint32_t number) noexcept { return {false, number}; }
+/// The processes of the members of the group of that number.
 constexpr BoardPeer group(std::uint32_t number) noexcept { return {true, number}; }
 /// The user of that number has this role at least.
 constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {user(number), role}; }
 /// Every member of the group of that number has at least this role.
 constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {group(number), role}; }
-/// The highest role that a gateway relays.
 struct GatewayBound {
     Role role;
 };
+/// The highest role that a gateway relays.
 constexpr GatewayBound up_to(Role role) noexcept { return {role}; }
-/// Marks a gateway whose users may be at the machine's panel.
 struct WithPanel {};
+/// Marks a gateway whose users may be at the machine's panel.
 inline constexpr WithPanel with_panel{};
 /// gateway(user(990), up_to(Role::machine_operator)): the processes of this user, or of this group, are
 /// gateways between the network and the machine.

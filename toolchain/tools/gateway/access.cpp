@@ -1,9 +1,20 @@
 // Logins from their beginning to a session, and what ends sessions.
 #include "toolchain/tools/gateway/access.hpp"
 
-#include <sys/stat.h>
-
 namespace tappet::network {
+
+namespace {
+
+/// Whether nothing changed, its mode and its owner included.
+bool is_same(const struct stat& one, const struct stat& other) {
+    const auto equal = [](const timespec& a, const timespec& b) {
+        return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+    };
+    return one.st_ino == other.st_ino && one.st_size == other.st_size && equal(one.st_mtim, other.st_mtim) &&
+           equal(one.st_ctim, other.st_ctim);
+}
+
+} // namespace
 
 bool Attempt::matches() const {
     const bool equal = are_equal(scrypt(password, user.salt, user.cost), user.hash);
@@ -14,8 +25,6 @@ Access::Access(std::string users_file, Users users)
     : path_{std::move(users_file)}, users_{std::move(users)}, pepper_{random_bytes(32)} {
     nobody_.salt = random_bytes(16);
     nobody_.hash = random_bytes(32);
-    struct stat state{};
-    if (::stat(path_.c_str(), &state) == 0) changed_ = state.st_mtim;
 }
 
 std::expected<Attempt, std::string> Access::begin(std::string_view user, std::string_view password,
@@ -50,7 +59,8 @@ std::expected<Access::Admitted, std::string> Access::finish(const Attempt& attem
 }
 
 std::optional<LoggedIn> Access::remembered(std::string_view user, std::string_view password,
-                                           Clock::time_point now) {
+                                           std::string_view address, Clock::time_point now) {
+    if (lockout_.left(user, address, now).count() > 0) return std::nullopt;
     const auto found = remembered_.find(sha256(pepper_ + std::string{user} + "\n" + std::string{password}));
     if (found == remembered_.end()) return std::nullopt;
     auto who = sessions_.find(found->second, now);
@@ -66,11 +76,16 @@ void Access::remember(std::string_view user, std::string_view password, const st
 std::string Access::refresh() {
     if (local_) return {};
     struct stat state{};
-    if (::stat(path_.c_str(), &state) != 0) return {};
-    if (state.st_mtim.tv_sec == changed_.tv_sec && state.st_mtim.tv_nsec == changed_.tv_nsec) return {};
-    changed_ = state.st_mtim;
+    const bool there = ::stat(path_.c_str(), &state) == 0;
+    if (there && fault_.empty() && is_same(state, read_)) return {};
     auto users = Users::read(path_);
-    if (!users) return "the users stay as they were: " + users.error();
+    if (!users) {
+        std::string fault = "the users stay as they were: " + users.error();
+        if (fault == fault_) return {};
+        return fault_ = std::move(fault);
+    }
+    fault_.clear();
+    read_ = state; // from before the reading: a change in between is read the next time
     for (const User& each : users_.all()) {
         const User* const now = users->find(each.name);
         if (now == nullptr || !(*now == each)) sessions_.end_of(each.name);

@@ -103,10 +103,13 @@ void Audit::rotate() {
 
 std::uint64_t Audit::asked(const Asked& asked) {
     rotate();
+    std::string line = as_utf8(std::string_view{asked.line}.substr(0, bounds.log_line));
+    if (asked.line.size() > bounds.log_line)
+        line += " .. cut, it has " + std::to_string(asked.line.size()) + " bytes";
     const bool written =
         write(head_of(++last_, "asked") + ", \"user\": " + in_quotes(asked.user) +
               ", \"address\": " + in_quotes(asked.address) + ", \"machine\": " + in_quotes(asked.machine) +
-              ", \"line\": " + in_quotes(as_utf8(asked.line)) +
+              ", \"line\": " + in_quotes(line) +
               ", \"before\": " + (asked.values.empty() ? "null" : asked.values) + "}\n");
     return written ? last_ : 0;
 }

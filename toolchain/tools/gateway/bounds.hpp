@@ -29,6 +29,7 @@ struct Bounds {
     std::size_t text_bytes = 1024;      ///< of a text value in a frame
     std::size_t requests_under_way = 32;
     std::chrono::seconds relay_idle{30};
+    std::size_t relays_of_client = 2; ///< connections to machines, a descriptor each
     // runs of browser's commands
     std::size_t runs = 8;
     std::size_t runs_of_user = 2;
@@ -56,6 +57,7 @@ struct Bounds {
     std::chrono::seconds lock_first{30};
     std::chrono::seconds lock_longest{15 * 60};
     // the log
+    std::size_t log_line = 512;              ///< of a request; more is cut
     std::size_t log_bytes = 4 * 1024 * 1024; ///< of a file
     unsigned log_files = 8;                  ///< the present one and its predecessors
     // the process

@@ -98,7 +98,7 @@ void Carriage::request(std::uint32_t id, const std::string& line, Clock::time_po
     }
     Pending pending{0, line, false, {}};
     if (verb == "subscribe") pending.event = line.substr(verb.size());
-    if (is_change(line)) {
+    if (who_.role != Role::observer && is_change(line)) {
         pending.logged =
             hub_.audit().asked({who_.user, address_, machine_, line, hub_.values_of(machine_, line)});
         if (pending.logged == 0)

@@ -122,6 +122,7 @@ void Hub::login(const std::string& user, const std::string& password, const std:
         done(std::move(outcome));
     };
     if (outside_.in_background([shared] { return shared->matches(); }, finish)) return;
+    access_.cancel(*shared);
     done(std::unexpected("too many people log in at once; try again"));
 }
 

@@ -66,12 +66,21 @@ void Lockout::fail(const std::string& key, Clock::time_point now) {
 
 void Lockout::succeed(std::string_view user, std::string_view address) {
     counts_.erase(key_of(user, address));
-    const auto of_address = counts_.find(key_of({}, address));
-    if (of_address == counts_.end()) return;
-    if (--of_address->second.failures == 0)
-        counts_.erase(of_address);
-    else if (of_address->second.failures < failures_of_address)
-        of_address->second.locked_until = {};
+    forgive(key_of({}, address), failures_of_address);
+}
+
+void Lockout::take_back(std::string_view user, std::string_view address) {
+    forgive(key_of(user, address), bounds.failures);
+    forgive(key_of({}, address), failures_of_address);
+}
+
+void Lockout::forgive(const std::string& key, unsigned allowed) {
+    const auto found = counts_.find(key);
+    if (found == counts_.end()) return;
+    if (--found->second.failures == 0)
+        counts_.erase(found);
+    else if (found->second.failures < allowed)
+        found->second.locked_until = {};
 }
 
 } // namespace tappet::network

@@ -20,6 +20,8 @@ public:
     /// Forgets the user's failures at this address. The address's own lose this one login only: who has one
     /// password gains no tries at others.
     void succeed(std::string_view user, std::string_view address);
+    /// Takes one begun login back, which could not be checked.
+    void take_back(std::string_view user, std::string_view address);
     [[nodiscard]] std::size_t size() const { return counts_.size(); }
 
 private:
@@ -28,6 +30,7 @@ private:
         Clock::time_point last{};
         Clock::time_point locked_until{};
     };
+    void forgive(const std::string& key, unsigned allowed);
     void fail(const std::string& key, Clock::time_point now);
 
     std::map<std::string, Count, std::less<>> counts_{};

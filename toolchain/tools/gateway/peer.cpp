@@ -111,12 +111,13 @@ void Peer::login(const Message& message, Clock::time_point now) {
     if (who_)
         return refuse(message.id, "not_now",
                       "this connection is logged in as " + who_->user + "; open another");
+    // One login at a time: a second would find the connection in use by the first.
+    if (logging_in_) return refuse(message.id, "not_now", "a login is being checked; wait for its answer");
     if (!message.session.empty()) {
         auto who = hub_.access().find(message.session, now);
         if (!who) return refuse(message.id, "denied", "the session is over; log in with user and password");
         return admit(message.id, std::move(*who), message.session);
     }
-    if (logging_in_) return refuse(message.id, "not_now", "a login is being checked; wait for its answer");
     logging_in_ = true;
     hub_.login(message.user, message.password, address_,
                [weak = weak_from_this(), id = message.id](auto outcome) {
@@ -159,6 +160,10 @@ void Peer::watch(const Message& message) {
                               "'; a watch has values of one machine, and \"facets\" lists them");
         watch.facets.push_back(found->index);
     }
+    std::vector<std::uint32_t> sorted = watch.facets;
+    std::ranges::sort(sorted);
+    if (std::ranges::adjacent_find(sorted) != sorted.end())
+        return refuse(message.id, "bad_request", "a value is named twice; name each once");
     watch.every = static_cast<unsigned>(std::lround(fastest / message.rate_hz));
     const auto types = [&](std::uint32_t facet) { return map.facets()[facet].type; };
     outlet_->send(
@@ -207,6 +212,10 @@ void Peer::request(const Message& message, Clock::time_point now) {
         return refuse(message.id, "not_now",
                       "a connection has at most " + std::to_string(bounds.requests_under_way) +
                           " requests and subscriptions under way; wait for an answer");
+    if (!carriages_.contains(message.machine) && carriages_.size() >= bounds.relays_of_client)
+        return refuse(message.id, "not_now",
+                      "a connection asks at most " + std::to_string(bounds.relays_of_client) +
+                          " machines at a time; wait " + std::to_string(bounds.relay_idle.count()) + " s");
     auto& carriage = carriages_[message.machine];
     if (carriage == nullptr)
         carriage =
@@ -220,7 +229,8 @@ void Peer::run(const Message& message) {
     Running running;
     for (const std::string& word : message.words)
         running.line += (running.line.empty() ? "" : " ") + browser::as_word(word);
-    if (!only_looks(message.words.empty() ? "" : message.words.front())) {
+    // An observer changes nothing: the machine refuses it, so it does not fill the log.
+    if (who_->role != Role::observer && !only_looks(message.words.empty() ? "" : message.words.front())) {
         running.logged =
             hub_.audit().asked({who_->user, address_, {}, running.line, hub_.values_of({}, running.line)});
         if (running.logged == 0)

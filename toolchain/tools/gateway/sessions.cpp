@@ -35,11 +35,11 @@ std::string Sessions::begin(const LoggedIn& who, Clock::time_point now) {
     return token;
 }
 
-std::optional<LoggedIn> Sessions::find(std::string_view token, Clock::time_point now) {
+std::optional<LoggedIn> Sessions::find(std::string_view token, Clock::time_point now, bool use) {
     expire(now);
     const auto found = all_.find(sha256(token));
     if (found == all_.end()) return std::nullopt;
-    found->second.used = now;
+    if (use) found->second.used = now;
     return found->second.who;
 }
 

@@ -21,8 +21,10 @@ class Sessions {
 public:
     /// Returns the token: 256 random bits in base64. The user's oldest session ends when there are too many.
     [[nodiscard]] std::string begin(const LoggedIn& who, Clock::time_point now);
-    /// Returns who has this token, and counts it as used; nothing: it is unknown, or its time is over.
-    [[nodiscard]] std::optional<LoggedIn> find(std::string_view token, Clock::time_point now);
+    /// Returns who has this token, and counts it as used if `use`; nothing: it is unknown, or its time is
+    /// over.
+    [[nodiscard]] std::optional<LoggedIn> find(std::string_view token, Clock::time_point now,
+                                               bool use = true);
     /// Returns whether the session lasts, without counting it as used.
     [[nodiscard]] bool lasts(std::string_view token, Clock::time_point now);
     void end(std::string_view token);

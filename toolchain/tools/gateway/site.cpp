@@ -92,11 +92,11 @@ std::string Site::fault_in_origin(const HttpRequest& request, bool needed) const
                                               "', not from here; open this gateway's own page";
 }
 
-std::optional<LoggedIn> Site::who(const HttpRequest& request, std::string& token) {
+std::optional<LoggedIn> Site::who(const HttpRequest& request, std::string& token, bool use) {
     if (hub_.access().local()) return hub_.access().local();
     const auto cookie = cookie_of(request.cookie, cookie_name());
     if (!cookie || cookie->empty()) return std::nullopt;
-    auto found = hub_.access().find(*cookie, Clock::now());
+    auto found = hub_.access().find(*cookie, Clock::now(), use);
     if (found) token = *cookie;
     return found;
 }
@@ -130,7 +130,7 @@ void Site::answer(const HttpRequest& request, OnReply reply) {
     if (target != "/" && target != "/login")
         return reply(plain(404, "there is /, /metrics, /v1 and /v1/schema.json"));
     std::string token;
-    const auto user = who(request, token);
+    const auto user = who(request, token, false); // the page refreshes itself, also when nobody looks at it
     if (!user) return reply({200, std::string{html}, login_page({}), {}});
     reply({200, std::string{html}, values_page(hub_.stations(), *user, !hub_.access().local()), {}});
 }
@@ -175,7 +175,8 @@ void Site::metrics(const HttpRequest& request, OnReply reply) {
     if (who(request, token)) return send(reply);
     const auto basic = basic_of(request.authorization);
     if (!basic) return reply(plain(401, "log in, or send user and password (basic_auth of Prometheus)"));
-    if (hub_.access().remembered(basic->user, basic->password, Clock::now())) return send(reply);
+    if (hub_.access().remembered(basic->user, basic->password, request.address, Clock::now()))
+        return send(reply);
     hub_.login(basic->user, basic->password, request.address,
                [this, basic, send, reply = std::move(reply)](auto outcome) {
                    if (!outcome) return reply(plain(401, outcome.error()));

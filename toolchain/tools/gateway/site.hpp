@@ -57,7 +57,8 @@ private:
     [[nodiscard]] std::string cookie_name() const { return encrypted_ ? "__Host-tappet" : "tappet"; }
     [[nodiscard]] std::string cookie(std::string_view token, bool over) const;
     [[nodiscard]] std::string fault_in_origin(const HttpRequest& request, bool needed) const;
-    [[nodiscard]] std::optional<LoggedIn> who(const HttpRequest& request, std::string& token);
+    [[nodiscard]] std::optional<LoggedIn> who(const HttpRequest& request, std::string& token,
+                                              bool use = true);
     void post(const HttpRequest& request, OnReply reply);
     void metrics(const HttpRequest& request, OnReply reply);
 

@@ -50,7 +50,7 @@ private:
     std::shared_ptr<const Place> place_{};
     std::string reason_{};
     std::uint32_t life_ = 0;
-    std::vector<std::uint16_t> wanted_{};
+    std::vector<std::uint32_t> wanted_{};
     std::vector<std::uint32_t> all_wanted_{}; ///< the facets that are wanted
     std::vector<browser::Reading> readings_{};
     std::int64_t machine_ns_ = -1;

@@ -8,7 +8,9 @@
 
 #include <array>
 #include <fstream>
+#include <functional>
 #include <sstream>
+#include <utility>
 
 #include <sys/stat.h>
 
@@ -92,6 +94,42 @@ TEST(UserCommand, adds_lists_changes_and_removes) {
     EXPECT_THAT(run({"remove", "mary"}), testing::StartsWith("0"));
     EXPECT_EQ(run({"list"}), "0 ");
     EXPECT_THAT(run({"delete", "mary"}), HasSubstr("user add NAME"));
+}
+
+/// A prompt at which somebody takes long: meanwhile something else happens.
+struct SlowPrompt : std::streambuf {
+    SlowPrompt(std::string what, std::function<void()> then)
+        : typed{std::move(what)}, meanwhile{std::move(then)} {}
+    int_type underflow() override {
+        if (!meanwhile) return traits_type::eof();
+        std::exchange(meanwhile, {})();
+        setg(typed.data(), typed.data(), typed.data() + typed.size());
+        return traits_type::to_int_type(typed.front());
+    }
+    std::string typed;
+    std::function<void()> meanwhile;
+};
+
+TEST(UserCommand, brings_nobody_back_who_was_removed_meanwhile) {
+    const test::Folder folder;
+    const std::string file = folder / "users";
+    Users users;
+    users.put(cheap("mallory", Role::engineer, "a long password"));
+    users.put(cheap("bob", Role::observer, "a long password"));
+    ASSERT_THAT(users.write(file), IsEmpty());
+    std::ostringstream out;
+    SlowPrompt prompt{"another password\nanother password\n", [&] {
+                          std::istringstream nothing;
+                          const std::vector<std::string_view> words{"remove", "mallory"};
+                          EXPECT_EQ(run_user_command(words, file, nothing, out, out), 0);
+                      }};
+    std::istream in{&prompt};
+    const std::vector<std::string_view> words{"password", "bob"};
+    EXPECT_EQ(run_user_command(words, file, in, out, out), 0) << out.str();
+    const auto left = Users::read(file);
+    ASSERT_TRUE(left);
+    EXPECT_EQ(left->find("mallory"), nullptr);
+    EXPECT_NE(*left->find("bob"), *users.find("bob"));
 }
 
 TEST(Secrets, follow_rfc_7914) {
@@ -245,15 +283,15 @@ TEST_F(Doors, count_many_attempts_at_once) {
 TEST_F(Doors, close_for_who_is_removed_or_changed) {
     const std::string token = login("mary", "a long password")->token;
     access->remember("mary", "a long password", token);
-    EXPECT_TRUE(access->remembered("mary", "a long password", now));
-    EXPECT_FALSE(access->remembered("mary", "another password", now));
+    EXPECT_TRUE(access->remembered("mary", "a long password", "10.0.0.1", now));
+    EXPECT_FALSE(access->remembered("mary", "another password", "10.0.0.1", now));
     EXPECT_THAT(access->refresh(), IsEmpty());
     EXPECT_TRUE(access->lasts(token, now));
     users.put(cheap("mary", Role::observer, "a long password"));
     ASSERT_THAT(users.write(file), IsEmpty());
     EXPECT_THAT(access->refresh(), IsEmpty());
     EXPECT_FALSE(access->lasts(token, now));
-    EXPECT_FALSE(access->remembered("mary", "a long password", now));
+    EXPECT_FALSE(access->remembered("mary", "a long password", "10.0.0.1", now));
     EXPECT_EQ(login("mary", "a long password")->who.role, Role::observer);
 }
 
@@ -263,6 +301,34 @@ TEST_F(Doors, stay_as_they_are_while_the_file_is_wrong) {
     EXPECT_THAT(access->refresh(), HasSubstr("the users stay as they were"));
     EXPECT_THAT(access->refresh(), IsEmpty()) << "said once";
     EXPECT_TRUE(access->lasts(token, now));
+}
+
+TEST_F(Doors, close_when_a_file_that_could_not_be_read_is_readable_again) {
+    const std::string token = login("mary", "a long password")->token;
+    users.remove("mary");
+    ASSERT_THAT(users.write(file), IsEmpty());
+    ASSERT_EQ(::chmod(file.c_str(), 0644), 0);
+    EXPECT_THAT(access->refresh(), HasSubstr("chmod 600"));
+    EXPECT_TRUE(access->lasts(token, now));
+    ASSERT_EQ(::chmod(file.c_str(), 0600), 0);
+    EXPECT_THAT(access->refresh(), IsEmpty());
+    EXPECT_FALSE(access->lasts(token, now));
+}
+
+TEST_F(Doors, open_by_no_remembered_password_at_a_locked_address) {
+    access->remember("mary", "a long password", login("mary", "a long password")->token);
+    for (unsigned i = 0; i < bounds.failures; ++i) EXPECT_FALSE(login("mary", "a wrong password"));
+    EXPECT_FALSE(access->remembered("mary", "a long password", "10.0.0.1", now));
+    EXPECT_TRUE(access->remembered("mary", "a long password", "10.0.0.2", now)) << "Prometheus is elsewhere";
+}
+
+TEST_F(Doors, stay_open_for_a_login_that_could_not_be_checked) {
+    for (unsigned i = 0; i < 3 * bounds.failures; ++i) {
+        const auto attempt = access->begin("mary", "a long password", "10.0.0.1", now);
+        ASSERT_TRUE(attempt) << attempt.error();
+        access->cancel(*attempt);
+    }
+    EXPECT_TRUE(login("mary", "a long password"));
 }
 
 } // namespace

@@ -112,6 +112,8 @@ TEST_F(Session, watches_within_bounds) {
     EXPECT_EQ(last()["ok"], true);
     say(R"({"id": 100, "do": "watch", "names": ["sample.shaft.angle", "sample.shaft.anlge"]})");
     EXPECT_EQ(last()["code"], "unknown");
+    say(R"({"id": 100, "do": "watch", "names": ["sample.shaft.angle", "sample.shaft.angle"]})");
+    EXPECT_EQ(last()["code"], "bad_request") << "twice";
     say(R"({"id": 100, "do": "watch", "names": ["sample.shaft.angle"], "rate_hz": 21})");
     EXPECT_EQ(last()["code"], "bad_value");
     rig.tick(20);
@@ -264,6 +266,25 @@ TEST(Requests, are_logged_with_values_and_outcome) {
     EXPECT_EQ(std::ranges::count(log, '\n'), 8) << log;
 }
 
+TEST(Requests, fill_the_log_neither_by_observers_nor_by_length) {
+    const test::Folder folder;
+    Rig rig{Access{LoggedIn{"mary", Role::engineer}}, folder / "log"};
+    ASSERT_THAT(rig.hub.audit().open([](const Asked&) { return std::string{}; }), IsEmpty());
+    Client client;
+    const auto eve = rig.join(client, LoggedIn{"eve", Role::observer});
+    eve->receive(R"({"id": 1, "do": "request", "machine": "sample", "line": "set shaft.gains.p 2"})",
+                 rig.now);
+    eve->receive(R"({"id": 2, "do": "run", "words": ["set", "shaft.gains.p", "2"]})", rig.now);
+    EXPECT_THAT(test::contents_of(folder / "log"), IsEmpty()) << "the machine refuses it";
+    Client other;
+    const auto mary = rig.join(other);
+    mary->receive(R"({"id": 1, "do": "run", "words": ["set", ")" + std::string(60'000, 'x') + R"("]})",
+                  rig.now);
+    const std::string log = test::contents_of(folder / "log");
+    EXPECT_THAT(log, HasSubstr(" .. cut, it has 60004 bytes"));
+    EXPECT_LT(log.size(), 2000u);
+}
+
 TEST(Requests, that_cannot_be_logged_are_not_sent) {
     Rig rig{Access{LoggedIn{"mary", Role::engineer}}, "/nowhere/log"};
     Client client;
@@ -302,6 +323,11 @@ TEST(Login, is_needed_first) {
     rig.checks.back()();
     EXPECT_EQ(client.texts.back()["role"], "operator");
     const std::string session = client.texts.back()["session"];
+    Client hasty;
+    const auto twofold = rig.join(hasty, std::nullopt);
+    say(twofold, R"({"id": 1, "do": "login", "user": "mary", "password": "a long password"})");
+    say(twofold, R"({"id": 2, "do": "login", "session": ")" + session + "\"}");
+    EXPECT_EQ(hasty.texts.back()["code"], "not_now") << "it would be two users at once";
     const auto second = rig.join(other, std::nullopt);
     say(second, R"({"id": 1, "do": "login", "session": ")" + session + "\"}");
     EXPECT_EQ(other.texts.back()["user"], "mary");
