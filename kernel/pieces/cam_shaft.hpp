@@ -28,7 +28,7 @@ namespace tappet {
 /// absence of codes (`wakes, stale_after(..)`). Real-time.
 template <const auto& cams> struct CamShaft {
     static constexpr std::size_t count = cams.size();
-    /// Of each row: the number of windows before it.
+    /// The number of windows before each row, and before the end.
     static constexpr auto window_of = [] {
         std::array<std::size_t, count + 1> before{};
         for (std::size_t i = 0; i < count; ++i) before[i + 1] = before[i] + (cams.rows[i].is_window ? 1 : 0);
