@@ -98,13 +98,16 @@ std::string label_text(std::string_view text) {
 std::string metrics_text(std::span<const Station* const> stations, const Counters& counters,
                          MetricsForm form) {
     std::string text;
-    family(text, "tappet_up", "gauge", "Whether the machine answers.");
+    const std::int64_t now_ns = monotonic_ns();
+    const auto lives = [&](const Station* each) {
+        return each->place() != nullptr && each->standstill(now_ns).empty();
+    };
+    family(text, "tappet_up", "gauge", "Whether the machine answers and makes cycles.");
     for (const Station* each : stations)
-        text += "tappet_up{machine=\"" + label_text(each->name()) + "\"} " +
-                (each->place() != nullptr ? "1" : "0") + "\n";
+        text += "tappet_up{machine=\"" + label_text(each->name()) + "\"} " + (lives(each) ? "1" : "0") + "\n";
     family(text, "tappet_value", "gauge", "A value of the machine, by its name; durations in seconds.");
     for (const Station* each : stations)
-        if (each->place() != nullptr) add_values(text, *each);
+        if (lives(each)) add_values(text, *each);
     family(text, "tappet_figure", "gauge",
            "What the framework counts for a part of the machine; durations in seconds.");
     for (const Station* each : stations)

@@ -80,7 +80,10 @@ std::string values_page(std::span<const Station* const> stations, const LoggedIn
             continue;
         }
         body += "<p>board " + in_html(each->place()->board) + ", build " + in_html(each->place()->build_id) +
-                "</p>\n<table>\n";
+                "</p>\n";
+        if (const std::string why = each->standstill(monotonic_ns()); !why.empty())
+            body += "<p>These values are old: " + in_html(why) + ".</p>\n";
+        body += "<table>\n";
         add_rows(body, *each);
         body += "</table>\n";
     }

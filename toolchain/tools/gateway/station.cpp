@@ -21,7 +21,7 @@ void Station::see(const Sighting& sighting) {
     all_wanted_.clear();
     readings_.assign(facets, {});
     machine_ns_ = -1;
-    advanced_ns_ = monotonic_ns();
+    advanced_ns_ = 0; // nothing was seen: very old
 }
 
 std::vector<std::uint32_t> Station::with_values() const {
@@ -54,9 +54,16 @@ std::vector<browser::Reading> Station::read(std::span<const std::uint32_t> facet
     return place_ == nullptr ? std::vector<browser::Reading>{} : observer().read(facets);
 }
 
+std::string Station::standstill(std::int64_t now_ns) const {
+    constexpr std::int64_t second = 1'000'000'000;
+    const std::int64_t age = age_ns(now_ns);
+    return age <= second ? "" : "its newest cycle is " + std::to_string(age / second) + " s old";
+}
+
 void Station::look(std::int64_t now_ns) {
-    if (place_ == nullptr || all_wanted_.empty()) return;
-    std::vector<browser::Reading> readings = read(all_wanted_);
+    if (place_ == nullptr) return;
+    std::vector<browser::Reading> readings;
+    if (!all_wanted_.empty()) readings = read(all_wanted_);
     for (browser::Reading& each : readings) {
         const std::uint32_t facet = each.facet;
         readings_[facet] = std::move(each);
@@ -65,7 +72,10 @@ void Station::look(std::int64_t now_ns) {
     std::int64_t newest = -1;
     for (const map::Activity& each : place_->map.activities())
         if (each.now_at != 0) newest = std::max(newest, place_->map.view().word<std::int64_t>(each.now_at));
-    if (newest != machine_ns_) advanced_ns_ = now_ns;
+    // A first look sees no advance. A machine in real time has our clock; another one is old until it
+    // advances.
+    if (newest != machine_ns_)
+        advanced_ns_ = machine_ns_ < 0 ? std::clamp(newest, std::int64_t{0}, now_ns) : now_ns;
     machine_ns_ = newest;
 }
 

@@ -40,6 +40,8 @@ public:
     [[nodiscard]] std::int64_t machine_ns() const { return machine_ns_; }
     /// Returns since when no newer cycle was seen: how old the newest look is.
     [[nodiscard]] std::int64_t age_ns(std::int64_t now_ns) const { return now_ns - advanced_ns_; }
+    /// Returns why the values are not live: the machine's newest cycle is older than 1 s; empty: they are.
+    [[nodiscard]] std::string standstill(std::int64_t now_ns) const;
     /// Reads single facets at once.
     [[nodiscard]] std::vector<browser::Reading> read(std::span<const std::uint32_t> facets) const;
     [[nodiscard]] browser::Observer observer() const;

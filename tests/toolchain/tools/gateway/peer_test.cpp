@@ -99,6 +99,17 @@ TEST_F(Session, sees_how_old_a_look_is) {
     EXPECT_GE(at<std::int64_t>(client.frames[1], 24), age + 20'000'000) << "the machine stands still";
 }
 
+TEST_F(Session, sees_at_once_that_a_machine_stood_still_before) {
+    rig.machine.set_now("shaft.angle", monotonic_ns() - 20'000'000'000);
+    rig.tick();
+    say(R"({"id": 5, "do": "watch", "names": ["sample.shaft.angle"], "rate_hz": 20})");
+    rig.tick();
+    EXPECT_GE(at<std::int64_t>(client.frames[0], 24), 20'000'000'000);
+    rig.machine.set_now("shaft.angle", monotonic_ns());
+    rig.tick();
+    EXPECT_LT(at<std::int64_t>(client.frames[1], 24), 1'000'000'000) << "it advances again";
+}
+
 TEST_F(Session, watches_within_bounds) {
     for (std::size_t i = 1; i <= bounds.watches; ++i)
         say("{\"id\": " + std::to_string(i) +
@@ -118,6 +129,23 @@ TEST_F(Session, watches_within_bounds) {
     EXPECT_EQ(last()["code"], "bad_value");
     rig.tick(20);
     EXPECT_THAT(client.frames, SizeIs(bounds.watches - 1)) << "once a second each";
+}
+
+TEST_F(Session, names_a_value_once_in_a_watch) {
+    say(R"({"id": 1, "do": "watch", "names": ["sample.shaft.angle", "sample.shaft.angle"]})");
+    EXPECT_EQ(last()["code"], "bad_request");
+    EXPECT_THAT(last()["error"].get<std::string>(), HasSubstr("twice"));
+}
+
+TEST_F(Session, keeps_its_values_when_one_of_65536_watchers_leaves) {
+    Station& station = *rig.hub.find("sample");
+    const std::uint32_t angle = station.with_values().front();
+    const std::vector<std::uint32_t> many(65'536, angle);
+    station.want(many);
+    station.drop(std::span{many}.first(1), station.life());
+    rig.machine.write("shaft.angle", 3.5, 99);
+    station.look(monotonic_ns());
+    EXPECT_EQ(station.reading(angle).stamp_ns, 99);
 }
 
 TEST_F(Session, hears_of_a_machine_that_ends) {

@@ -72,6 +72,9 @@ TEST(Sandbox, leaves_no_other_program_process_or_network) {
             return 5;
         if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0) return 6;
         if (::setuid(0) == 0 || ::kill(::getppid(), 0) == 0) return 7;
+        const pid_t parent = ::getppid();
+        if (::syscall(SYS_tgkill, parent, parent, 0) == 0 || ::syscall(SYS_tkill, parent, 0) == 0) return 11;
+        if (::syscall(SYS_tgkill, ::getpid(), ::gettid(), 0) != 0) return 12;
         if (::listen(local, 1) == 0) return 8;
         const rlimit more{4096, 4096};
         if (::setrlimit(RLIMIT_NOFILE, &more) == 0) return 9;

@@ -134,6 +134,10 @@ TEST_F(Guarded, gives_metrics_to_prometheus_by_its_password) {
     };
     EXPECT_EQ(scrape("a wrong password").status, 401u);
     EXPECT_EQ(scrape("a long password").status, 200u);
+    EXPECT_THAT(scrape("a long password").body, HasSubstr("tappet_up{machine=\"sample\"} 0\n"))
+        << "it stands";
+    rig.machine.set_now("shaft.angle", monotonic_ns());
+    rig.hub.tick(rig.now);
     bool checked = false;
     rig.checks.emplace_back([&] { checked = true; });
     EXPECT_THAT(scrape("a long password").body, HasSubstr("tappet_up{machine=\"sample\"} 1\n"));
@@ -166,6 +170,8 @@ TEST(Loopback, trusts_no_other_name) {
 TEST(Metrics, leave_out_what_is_not_known) {
     Rig rig;
     rig.machine.write("shaft.angle", 12.5);
+    rig.machine.set_now("shaft.angle", monotonic_ns());
+    rig.tick();
     const auto text = [&] { return metrics_text(rig.hub.stations(), rig.hub.counters(), MetricsForm::open); };
     EXPECT_THAT(text(),
                 HasSubstr("tappet_value{machine=\"sample\",name=\"shaft.angle\",unit=\"deg\"} 12.5\n"));
