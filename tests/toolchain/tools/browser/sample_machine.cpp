@@ -191,7 +191,8 @@ map::Section SampleMap::lay(std::vector<std::byte>& block, const std::vector<Rec
     section.at = static_cast<std::uint32_t>((header_.map_bytes + 7) / 8 * 8);
     section.count = static_cast<std::uint32_t>(records.size());
     section.stride = sizeof(Record);
-    std::memcpy(block.data() + section.at, records.data(), records.size() * sizeof(Record));
+    if (!records.empty())
+        std::memcpy(block.data() + section.at, records.data(), records.size() * sizeof(Record));
     header_.map_bytes = section.at + records.size() * sizeof(Record);
     return section;
 }
