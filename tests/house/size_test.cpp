@@ -45,7 +45,7 @@ const std::vector<Size> sizes{
     {"tests/kernel",         33196},
     {"tests/drivers",         19360},
     {"tests/apps",            6193},
-    {"tests/toolchain",       9003},
+    {"tests/toolchain",       9004},
     {"tests/bench",           4779},
     {"tests/diagnostics",     4662},
     {"tests/differential",    4851},
