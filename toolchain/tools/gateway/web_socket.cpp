@@ -4,6 +4,7 @@
 #include "toolchain/tools/gateway/encoding.hpp"
 #include "toolchain/tools/gateway/peer.hpp"
 
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 
@@ -40,10 +41,13 @@ template <class Handler> void async_teardown(boost::beast::role_type role, WireR
     async_teardown(role, wire.wire(), std::forward<Handler>(handler));
 }
 
+/// How long a WebSocket that ends may still write; then its socket is closed.
+constexpr std::chrono::seconds farewell{2};
+
 class WebSocket : public Outlet, public std::enable_shared_from_this<WebSocket> {
 public:
     WebSocket(std::unique_ptr<Wire> wire, std::shared_ptr<void> place)
-        : stream_{std::move(wire)}, place_{std::move(place)} {}
+        : stream_{std::move(wire)}, limit_{stream_.get_executor()}, place_{std::move(place)} {}
 
     void start(const http::request<http::string_body>& request, Hub& hub, Admission admission,
                std::string address) {
@@ -84,6 +88,8 @@ public:
     void end(std::string_view reason) override {
         if (std::exchange(ending_, true)) return;
         reason_ = cut(reason, 120);
+        // A client that reads nothing holds neither a write nor the farewell up.
+        close_after(farewell);
         // Later: the caller may be the peer itself.
         net::post(stream_.get_executor(), [self = shared_from_this()] {
             if (self->queue_.size() > 1) self->queue_.resize(1); // the one under way
@@ -96,6 +102,14 @@ private:
         std::string bytes{};
         bool is_binary = false;
     };
+
+    void close_after(std::chrono::seconds most) {
+        limit_.expires_after(most);
+        limit_.async_wait([weak = weak_from_this()](error_code error) {
+            const auto self = weak.lock();
+            if (!error && self != nullptr) self->stream_.next_layer().wire().close();
+        });
+    }
 
     void read() {
         stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
@@ -147,6 +161,7 @@ private:
     }
 
     websocket::stream<WireRef, false> stream_;
+    net::steady_timer limit_;
     std::shared_ptr<void> place_;
     std::shared_ptr<Peer> peer_{};
     boost::beast::flat_buffer buffer_{bounds.message_bytes + 1024};
